@@ -99,11 +99,7 @@ fn entry(key: &str, value: &Value) -> Option<String> {
             let wanted = format!("a list of some of {}", REPAIRS.join(", "));
             must(key, value, value.as_array().is_some_and(known), &wanted)
         }
-        "missing" => {
-            let is_text = |v: &Value| v.as_str().is_some_and(|text| !text.parse::<f64>().is_ok_and(f64::is_finite));
-            let all = value.as_array().is_some_and(|all| !all.is_empty() && all.iter().all(is_text));
-            must(key, value, all, "a list of texts that are no numbers, like [\"NaN\", \"OVLD\"]")
-        }
+        "missing" => missing(value),
         "select" => {
             let simple = |v: &Value| v.is_string() || v.is_number() || v.is_boolean();
             let several = |v: &Value| v.as_array().is_some_and(|all| !all.is_empty() && all.iter().all(simple));
@@ -135,6 +131,12 @@ fn task(value: &Value) -> Option<String> {
         known,
         &format!("one of block-stack, crank, needle, mechanism, barrel, switch and payload{own}"),
     )
+}
+
+fn missing(value: &Value) -> Option<String> {
+    let is_text = |v: &Value| v.as_str().is_some_and(|text| !text.parse::<f64>().is_ok_and(f64::is_finite));
+    let are_texts = value.as_array().is_some_and(|all| !all.is_empty() && all.iter().all(is_text));
+    must("missing", value, are_texts, "a list of texts that are no numbers, like [\"NaN\", \"OVLD\"]")
 }
 
 fn hand_member(key: &str, value: &Value) -> Option<String> {

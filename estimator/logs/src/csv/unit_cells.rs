@@ -134,16 +134,16 @@ fn is_number(cell: &str) -> bool {
     value(cell).is_some()
 }
 
-/// A number times a factor, with the same decimal mark.
-fn times(number: &str, factor: f64) -> String {
-    let product = value(number).map_or_else(|| number.to_owned(), |value| (value * factor).to_string());
+/// A number in another unit, with the same decimal mark.
+fn times(number: &str, [factor, own]: [f64; 2]) -> String {
+    let product = value(number).map_or_else(|| number.to_owned(), |value| (value * factor / own).to_string());
     if number.contains(',') { product.replace('.', ",") } else { product }
 }
 
-/// Ratio of two units that measure the same mechanical quantity.
-fn ratio(unit: &str, own: &str) -> Option<f64> {
+/// SI values of two units that measure the same mechanical quantity.
+fn ratio(unit: &str, own: &str) -> Option<[f64; 2]> {
     match (parse(unit, &[]), parse(own, &[])) {
-        (Written::Known(a, factor), Written::Known(b, own)) if a == b && a != Dimension::Other => Some(factor / own),
+        (Written::Known(a, factor), Written::Known(b, own)) if a == b && a != Dimension::Other => Some([factor, own]),
         _ => None,
     }
 }

@@ -12,7 +12,8 @@ const BITS_OF_FORCE: i32 = 16;
 const ROUND: [f64; 4] = [1.0, 2.0, 5.0, 10.0];
 /// Least share of a counter's range that its values fill if it ran over.
 const FILLED: f64 = 0.9;
-/// Usual step of a force in one sample, as a share of the range. Dry friction that reverses makes larger ones.
+/// Usual step in one sample of a force, and of a scale of round length, as a share of the range. Dry friction that reverses makes
+/// larger ones.
 const STEP: f64 = 0.1;
 /// Least share of overruns beside which the step is a usual one.
 const USUAL: f64 = 0.5;
@@ -73,14 +74,12 @@ fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
         return None;
     }
     let unit = unit(values);
-    if is_force && unit.is_none() {
-        return None;
-    }
     let fits = |range: &f64| span < *range && span >= FILLED * range;
     let least = if is_force { BITS_OF_FORCE } else { 0 };
-    let binary = BITS.into_iter().filter(|bits| *bits >= least).filter_map(|bits| Some(unit? * 2_f64.powi(bits)));
+    let of_bits = |unit: f64| BITS.iter().filter(|bits| **bits >= least).map(move |bits| unit * 2_f64.powi(*bits));
+    let binary = unit.and_then(|unit| of_bits(unit).find(fits));
+    let range = binary.or_else(|| round_range(span).filter(|range| !is_force && fits(range)))?;
     let unit = unit.unwrap_or(0.0);
-    let range = binary.chain(round_range(span).filter(|_| !is_force)).find(fits)?;
     // A force counts from an end of its range, or from the middle; the origin of a position may have been moved.
     let begins_at = |start: f64| low >= start - 0.5 * unit && high < start + range + 0.5 * unit;
     if is_force && ![0.0, -0.5 * range, -range].into_iter().any(begins_at) {
@@ -92,7 +91,7 @@ fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
         let step = |i: usize| values.get(i).map_or(0.0, |value| (value - values[i - 1]).abs());
         let usual = if i > 1 { step(i - 1) } else { 0.0 }.max(step(i + 1));
         let most = if is_force { STEP * range } else { 2.0 * usual + 2.0 * unit };
-        (step(i) - range).abs() <= most
+        (step(i) - range).abs() <= most && (binary.is_some() || usual <= STEP * range)
     };
     let share = if is_force { USUAL } else { 1.0 };
     let is_smooth = leaps.iter().filter(|leap| goes_on(leap)).count() as f64 >= share * leaps.len() as f64;
