@@ -37,7 +37,7 @@ fn as_entries(value: Value) -> Option<Suggested> {
     if let Value::Object(entries) = value { Some(entries) } else { None }
 }
 
-/// Puts entries into those of a sidecar. Objects are joined, and factors of `scale` are multiplied.
+/// Puts entries into those of a sidecar. Objects and lists are joined, and factors of `scale` are multiplied.
 pub fn put_into(entries: &Suggested, sidecar: &mut Suggested) {
     for (key, value) in entries {
         match (sidecar.get_mut(key), value) {
@@ -51,6 +51,7 @@ pub fn put_into(entries: &Suggested, sidecar: &mut Suggested) {
                     there.insert(name.clone(), value);
                 }
             }
+            (Some(Value::Array(there)), Value::Array(new)) => there.extend(new.iter().cloned()),
             _ => {
                 sidecar.insert(key.clone(), value.clone());
             }
@@ -99,9 +100,9 @@ mod tests {
     #[test]
     fn entries_are_joined() {
         let entries = |value: Value| as_entries(value).expect("an object");
-        let mut sidecar = entries(json!({ "task": "crank", "scale": { "f_N": 2.0, "q_m": 1.5 } }));
-        put_into(&entries(json!({ "scale": { "q_m": 0.001 }, "rate_hz": null })), &mut sidecar);
-        let joined = json!({ "task": "crank", "scale": { "f_N": 2.0, "q_m": 0.0015 }, "rate_hz": null });
+        let mut sidecar = entries(json!({ "task": "crank", "scale": { "f_N": 2.0, "q_m": 1.5 }, "missing": ["--"] }));
+        put_into(&entries(json!({ "scale": { "q_m": 0.001 }, "rate_hz": null, "missing": ["NaN"] })), &mut sidecar);
+        let joined = json!({ "task": "crank", "scale": { "f_N": 2.0, "q_m": 0.0015 }, "missing": ["--", "NaN"], "rate_hz": null });
         assert_eq!(Value::Object(sidecar), joined);
     }
 }
