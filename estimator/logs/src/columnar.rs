@@ -21,7 +21,7 @@ pub fn table(raw: &mut Raw, plan: &Plan, path: &Path) -> Result<Table, LogError>
     }
     let mut rows = selected(raw, plan, path)?;
     let mut table = Table::default();
-    leave_missing_out(raw, plan, &mut rows, &mut table);
+    leave_missing_out(raw, plan, &mut rows, &mut table, path)?;
     fingerprint(raw, plan, &mut table);
     let groups = groups(raw, plan, &rows);
     let uses = usable(raw, plan, &groups, &mut table, path)?;
@@ -113,7 +113,13 @@ fn selected(raw: &Raw, plan: &Plan, path: &Path) -> Result<Vec<usize>, LogError>
 }
 
 /// Leaves out the rows in which a needed column holds a text that stands for no measurement.
-fn leave_missing_out(raw: &Raw, plan: &Plan, rows: &mut Vec<usize>, table: &mut Table) {
+fn leave_missing_out(
+    raw: &Raw,
+    plan: &Plan,
+    rows: &mut Vec<usize>,
+    table: &mut Table,
+    path: &Path,
+) -> Result<(), LogError> {
     let needed = plan.uses.iter().zip(&raw.columns).zip(&raw.headers);
     for ((wanted, cells), header) in needed.filter(|_| !plan.missing.is_empty()) {
         if !matches!(wanted, Use::Number { required: true, .. }) {
@@ -122,10 +128,22 @@ fn leave_missing_out(raw: &Raw, plan: &Plan, rows: &mut Vec<usize>, table: &mut 
         let before = rows.len();
         let is_out = |row: usize| !number(cells, row).is_finite() && plan.is_missing(cells.text(row).trim());
         rows.retain(|row| !is_out(*row));
+        if rows.is_empty() && before > 0 {
+            return Err(LogError::BadCell {
+                row: 1,
+                line: 0,
+                column: header.clone(),
+                what: "no row holds a value".into(),
+                advice: MAP_ANOTHER,
+                mend: None,
+                path: path.to_path_buf(),
+            });
+        }
         if rows.len() < before {
             table.notes.push(format!("{} row(s) without a value of `{header}` are left out", before - rows.len()));
         }
     }
+    Ok(())
 }
 
 /// Rows by trial, in the order in which the trials first appear.

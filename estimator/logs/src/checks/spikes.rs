@@ -223,6 +223,10 @@ fn is_spike(
     if there * back >= 0.0 || height < least || (values[end] - values[at - 1]).abs() > RETURN_SHARE * height {
         return false;
     }
+    // Three samples of a blow differ, those of a spike hardly.
+    if run.len() == LONGEST && values[run.clone()].iter().any(|v| (v - values[at]).abs() > RETURN_SHARE * height) {
+        return false;
+    }
     let is_small = |step: f64| SPIKE_STEPS * step.abs() < height;
     // The top of a slope has one at its side; a spike has a sample as far away as itself there only if that is another one.
     let before = (at.saturating_sub(LONGEST + 2)..at - 1).map(|i| values[at - 1] - values[i]);
@@ -290,6 +294,7 @@ mod tests {
         assert_eq!(found(&with(&[1.0])), [AT]);
         assert_eq!(found(&with(&[1.0, 1.01])), [AT, AT + 1]);
         assert_eq!(found(&with(&[1.0, 1.01, 0.99])), [AT, AT + 1, AT + 2]);
+        assert_eq!(found(&with(&[0.2, 1.4, 0.0])), [0; 0]);
         // Two with one sample between them.
         assert_eq!(found(&with(&[1.0, -1.0, 1.0])), [AT, AT + 2]);
         assert_eq!(found(&with(&[-0.7, -0.4, 0.0, -0.45, -0.75])), [0; 0]);

@@ -41,18 +41,22 @@ fn named(parts: &[String], headers: &[String]) -> Vec<String> {
 /// Words for a unit in the name of a fact.
 const UNIT_WORDS: [&str; 4] = ["units", "unit", "einheiten", "einheit"];
 /// Words for a conversion of counts.
-const COUNTS: [&str; 7] = ["counts per", "count per", "per count", "counts/", "/count", "1 count ", "lsb"];
+const COUNTS: [&str; 6] = ["counts per", "count per", "per count", "1 count ", "1 lsb", "per lsb"];
 
 /// Units that lines such as `Load units: kN` state for columns by their names, and sentences about them, about units of other
-/// quantities, and about conversions of counts. `lines`: those above the names; `units`: texts that are known already.
+/// quantities, and about conversions of counts. `lines`: those above the names; `units`: texts that are known already; `has_scale`: the
+/// user has stated factors.
 pub fn facts<'a>(
     lines: impl Iterator<Item = &'a str>,
     headers: &[String],
     units: &mut Vec<String>,
-    delimiter: u8,
+    (delimiter, has_scale): (u8, bool),
 ) -> Vec<String> {
     let mut said = Vec::new();
-    for line in lines.map(|line| line.trim_start_matches(['#', ' ']).trim()) {
+    // Spreadsheets pad lines with delimiters.
+    let trimmed =
+        |line: &'a str| line.trim_start_matches(['#', ' ']).trim_end_matches(['\r', char::from(delimiter)]).trim();
+    for line in lines.map(trimmed) {
         let mut parts = line.splitn(2, [':', '=', char::from(delimiter)]).map(|part| part.trim().trim_matches('"'));
         let (Some(key), Some(value)) = (parts.next(), parts.next()) else { continue };
         let of = of_unit(&key.to_lowercase());
@@ -63,13 +67,14 @@ pub fn facts<'a>(
             if let Some(&column) = open.iter().find(|k| headers[**k].eq_ignore_ascii_case(&of)) {
                 value.clone_into(&mut units[column]);
                 said.push(format!("the unit of `{}` is that of the line `{line}` above the names", headers[column]));
-            } else if !open.is_empty() && factor != 1.0 {
+            } else if !open.is_empty() && factor != 1.0 && !has_scale {
                 said.push(format!(
                     "the line `{line}` above the names states a unit, and no column without a unit has that name: if a mapped \
                      column is in it, state its factor to SI units with \"scale\" in the sidecar"
                 ));
             }
-        } else if COUNTS.iter().any(|words| line.to_lowercase().contains(words))
+        } else if !has_scale
+            && COUNTS.iter().any(|words| line.to_lowercase().contains(words))
             && line.contains(|c: char| c.is_ascii_digit())
         {
             said.push(format!(
@@ -139,11 +144,13 @@ mod tests {
             ("Force Units: N", "", ""),
             ("Counts per Unit Force: 320.0", "", "conversion of counts"),
             ("# load cell: 1 count = 0.005 N", "", "conversion of counts"),
+            ("Load units: kN,,", "kN", "is that of the line"),
+            ("# Operator: Elsbeth, rig 2", "", ""),
             ("Sample count: 2000", "", ""),
             ("Operator: N", "", ""),
         ] {
             let mut units = Vec::new();
-            let said = facts(std::iter::once(line), &headers, &mut units, b',');
+            let said = facts(std::iter::once(line), &headers, &mut units, (b',', false));
             assert_eq!(units.get(2).map_or("", String::as_str), unit, "{line}");
             assert!(
                 said.len() == usize::from(!word.is_empty()) && said.iter().all(|text| text.contains(word)),

@@ -261,13 +261,14 @@ fn divided(text: &[u8], comments: &[u8], (delimiter, is_stated): (u8, bool), met
         dialect.notes.push(format!("the units are those of the comment `{comment}`"));
     }
     let lines = &records[..found.header.unwrap_or(0)];
-    if meta.is_none_or(|meta| meta.scale.is_empty()) {
-        let comments = String::from_utf8_lossy(comments);
-        let lines = lines.iter().map(|line| String::from_utf8_lossy(&text[line.start..line.end]));
-        let lines: Vec<Cow<'_, str>> = comments.lines().map(Cow::from).chain(lines).collect();
-        let facts = above::facts(lines.iter().map(AsRef::as_ref), &dialect.headers, &mut dialect.units, delimiter);
-        dialect.notes.extend(facts);
-    }
+    let texts = String::from_utf8_lossy(comments);
+    let texts = texts.lines().map(Cow::from);
+    let texts = texts.chain(lines.iter().map(|line| String::from_utf8_lossy(&text[line.start..line.end])));
+    let texts: Vec<Cow<'_, str>> = texts.collect();
+    let has_scale = meta.is_some_and(|meta| !meta.scale.is_empty());
+    let above = texts.iter().map(AsRef::as_ref);
+    let facts = above::facts(above, &dialect.headers, &mut dialect.units, (delimiter, has_scale));
+    dialect.notes.extend(facts);
     dialect.notes.extend(lines.iter().find_map(|line| above::factors(&line.cells, found.width, notation)));
     take_upper_names(&mut dialect.headers, lines);
     let header = found.header.map_or(0, |k| records[k].line);

@@ -4,8 +4,9 @@
 use super::cells::{Notation, number};
 use super::decimal::Decimal;
 use super::layout;
+use crate::plan::is_like_a_clock;
 use crate::units::Dimension;
-use crate::written_units::{Written, parse};
+use crate::written_units::{Written, in_header, parse};
 use haptics::recording::Meta;
 use std::borrow::Cow;
 
@@ -16,6 +17,8 @@ pub struct UnitCells {
     pub units: Vec<String>,
     /// True for a column whose unit stands in the next one.
     in_next: Vec<bool>,
+    /// True if the numbers have decimal commas.
+    has_comma: bool,
 }
 
 /// Columns whose cells are text, though it may look like a number with a unit: a label of `0"` is no length.
@@ -45,15 +48,7 @@ fn with_delimiter(start: &[u8], delimiter: u8, texts: &[&str]) -> Option<UnitCel
         let mut cells = records.iter().filter_map(|record| record.cells.get(column));
         cells.any(|cell| texts.contains(&cell.as_str()))
     };
-    let is_unit_column = |column: usize| {
-        let name = records[0].cells.get(column).map_or("", String::as_str).to_lowercase();
-        let is_same = |record: &layout::Record| ratio(&record.cells[column], &later[0].cells[column]).is_some();
-        let is_named = ["unit", "einheit"].iter().any(|word| name.contains(word)) || is_mechanical(&name);
-        is_named && is_mechanical(&later[0].cells[column]) && later.iter().all(is_same)
-    };
-    let is_number = |column: usize| later.iter().all(|record| is_number(&record.cells[column]));
-    let in_next = (0..width).map(|column| column + 1 < width && is_unit_column(column + 1) && is_number(column));
-    let in_next: Vec<bool> = in_next.collect();
+    let in_next = columns_with_unit_in_next(&records[0], later);
     let unit = |column: usize| {
         if is_text(column) || in_next[column] {
             return in_next[column].then(|| later[0].cells[column + 1].clone());
@@ -65,9 +60,39 @@ fn with_delimiter(start: &[u8], delimiter: u8, texts: &[&str]) -> Option<UnitCel
         (is_known && units.all(fits)).then(|| unit.to_owned())
     };
     let units: Vec<String> = (0..width).map(|column| unit(column).unwrap_or_default()).collect();
-    let found = UnitCells { delimiter, units, in_next };
+    let has_comma = later.iter().flat_map(|record| &record.cells).any(|cell| cell.contains(',') && !cell.contains('.'));
+    let found = UnitCells { delimiter, units, in_next, has_comma };
     let is_one = found.with_units().next().is_some() && !records.iter().any(|record| found.has_other_units(record));
     is_one.then_some(found)
+}
+
+/// True for each column of numbers whose unit stands in the next one. `names`: the first record; `later`: rows.
+fn columns_with_unit_in_next(names: &layout::Record, later: &[layout::Record]) -> Vec<bool> {
+    let width = later[0].cells.len();
+    let name = |column: usize| names.cells.get(column).map_or("", String::as_str);
+    let holds_numbers = |column: usize| column < width && later.iter().all(|record| is_number(&record.cells[column]));
+    let holds_units = |column: usize| {
+        let first = later[0].cells.get(column).map_or("", String::as_str);
+        is_mechanical(first) && later.iter().all(|record| ratio(&record.cells[column], first).is_some())
+    };
+    let is_pair = |column: usize| {
+        let (own, next) = (name(column), name(column + 1).to_lowercase());
+        if !holds_units(column + 1)
+            || !holds_numbers(column)
+            || !in_header(own, &[]).1.is_empty()
+            || is_like_a_clock(own)
+        {
+            return false;
+        }
+        let of = next.split([' ', '_', '.', '-']).filter(|word| !["unit", "units", "einheit"].contains(word));
+        let of = of.collect::<Vec<_>>().join("_");
+        // A unit between two numbers may be that of the second.
+        let is_last = !holds_numbers(column + 2) || holds_units(column + 3);
+        let has_word = next.contains("unit") || next.contains("einheit");
+        has_word && !of.is_empty() && own.to_lowercase().starts_with(&of)
+            || is_last && (has_word && of.is_empty() || is_mechanical(&next))
+    };
+    (0..width).map(is_pair).collect()
 }
 
 impl UnitCells {
@@ -82,6 +107,12 @@ impl UnitCells {
             && self
                 .with_units()
                 .any(|(column, own)| unit_of(column).is_none_or(|unit| unit != own && ratio(unit, own).is_none()))
+    }
+
+    /// A number in another unit, with the decimal mark of the table.
+    fn times(&self, number: &str, [factor, own]: [f64; 2]) -> String {
+        let product = value(number).map_or_else(|| number.to_owned(), |value| (value * factor / own).to_string());
+        if self.has_comma { product.replace('.', ",") } else { product }
     }
 
     /// A number of a record and its unit.
@@ -105,7 +136,7 @@ impl UnitCells {
                 let cell = match number {
                     Some((number, unit)) if unit == own => Cow::from(number),
                     Some((number, unit)) => Cow::from(
-                        ratio(unit, own).map_or_else(|| format!("{number} {unit}"), |ratio| times(number, ratio)),
+                        ratio(unit, own).map_or_else(|| format!("{number} {unit}"), |ratio| self.times(number, ratio)),
                     ),
                     None => Cow::from(cell),
                 };
@@ -132,12 +163,6 @@ fn value(cell: &str) -> Option<f64> {
 
 fn is_number(cell: &str) -> bool {
     value(cell).is_some()
-}
-
-/// A number in another unit, with the same decimal mark.
-fn times(number: &str, [factor, own]: [f64; 2]) -> String {
-    let product = value(number).map_or_else(|| number.to_owned(), |value| (value * factor / own).to_string());
-    if number.contains(',') { product.replace('.', ",") } else { product }
 }
 
 /// SI values of two units that measure the same mechanical quantity.
@@ -172,6 +197,11 @@ mod tests {
         assert_eq!(found.units, ["", "kN", "", ""]);
         let plain = String::from_utf8(found.taken_out(text)).expect("text");
         assert!(plain.contains("3,1.8,kN,N\n4,1.9,N,N\n5,2 mm,mm,N\n"), "{plain}");
+        let before = b"time,unit,value,pos_mm\n0,N,1,2\n1,N,2,2\n2,N,1,3\n3,N,1,4\n4,N,1,4\n";
+        assert!(of(before, None).is_none(), "the unit of a number behind it");
+        let commas = "t_s;f\n0;1,5 kN\n1;2,5 kN\n2;3,5 kN\n3;900 N\n4;1234 N\n5;2,5 kN\n";
+        let plain = of(commas.as_bytes(), None).expect("units").taken_out(commas.as_bytes());
+        assert!(String::from_utf8_lossy(&plain).contains("3;0,9\n4;1,234\n"), "{}", String::from_utf8_lossy(&plain));
         assert!(of(b"t_s,force,flag\n0,1,N\n1,2,N\n2,3,N\n3,4,N\n", None).is_none());
     }
 

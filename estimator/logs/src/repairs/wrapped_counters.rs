@@ -29,8 +29,9 @@ const ROUNDING: f64 = 1e-7;
 /// Lets the values of counters go on where they ran over.
 pub fn unwrap(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
+    let gaps = gaps(recording);
     for k in 0..recording.channels.len() {
-        let Some((range, overruns)) = overruns(&recording.channels[k]) else { continue };
+        let Some((range, overruns)) = overruns(&recording.channels[k], &gaps) else { continue };
         let channel = &recording.channels[k];
         let text = format!(
             "{} runs over the end of its counter {} time(s), first at {}: its values go on from there",
@@ -59,8 +60,17 @@ fn go_on(channel: &mut Channel, range: f64, overruns: &[usize]) {
     }
 }
 
-/// Range of a counter that ran over, and the samples at which it did.
-fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
+/// True for the rows behind a gap of the clock, and for all rows without a clock: a position may be another one there.
+fn gaps(recording: &Recording) -> Vec<bool> {
+    let Some(time) = &recording.time_s else { return vec![true; recording.len()] };
+    let mut steps: Vec<f64> = time.windows(2).map(|w| w[1] - w[0]).collect();
+    let middle = steps.len() / 2;
+    let usual = if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    std::iter::once(true).chain(time.windows(2).map(|w| w[1] - w[0] > 2.0 * usual)).collect()
+}
+
+/// Range of a counter that ran over, and the samples at which it did. A scale of round length does so only where the clock runs on.
+fn overruns(channel: &Channel, gaps: &[bool]) -> Option<(f64, Vec<usize>)> {
     let values = channel.values.as_slice();
     let is_force = matches!(channel.unit.as_str(), "N" | "Nm");
     if values.len() < 3 || !(is_position(channel) || is_force && units::is_program_name(&channel.name)) {
@@ -78,7 +88,8 @@ fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
     let least = if is_force { BITS_OF_FORCE } else { 0 };
     let of_bits = |unit: f64| BITS.iter().filter(|bits| **bits >= least).map(move |bits| unit * 2_f64.powi(*bits));
     let binary = unit.and_then(|unit| of_bits(unit).find(fits));
-    let range = binary.or_else(|| round_range(span).filter(|range| !is_force && fits(range)))?;
+    let runs_on = || !is_force && leaps.iter().all(|leap| !gaps[*leap]);
+    let range = binary.or_else(|| round_range(span).filter(|range| fits(range) && runs_on()))?;
     let unit = unit.unwrap_or(0.0);
     // A force counts from an end of its range, or from the middle; the origin of a position may have been moved.
     let begins_at = |start: f64| low >= start - 0.5 * unit && high < start + range + 0.5 * unit;
@@ -91,7 +102,9 @@ fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
         let step = |i: usize| values.get(i).map_or(0.0, |value| (value - values[i - 1]).abs());
         let usual = if i > 1 { step(i - 1) } else { 0.0 }.max(step(i + 1));
         let most = if is_force { STEP * range } else { 2.0 * usual + 2.0 * unit };
-        (step(i) - range).abs() <= most && (binary.is_some() || usual <= STEP * range)
+        // A leap beside another one is no overrun.
+        let largest = if binary.is_some() { 0.5 * span } else { STEP * range };
+        (step(i) - range).abs() <= most && (is_force || usual <= largest)
     };
     let share = if is_force { USUAL } else { 1.0 };
     let is_smooth = leaps.iter().filter(|leap| goes_on(leap)).count() as f64 >= share * leaps.len() as f64;
@@ -102,7 +115,7 @@ fn overruns(channel: &Channel) -> Option<(f64, Vec<usize>)> {
 /// The smallest round number above a span: the length of a scale that starts anew.
 fn round_range(span: f64) -> Option<f64> {
     let decade = 10_f64.powf(span.log10().floor());
-    ROUND.into_iter().map(|round| round * decade).find(|range| *range > span)
+    ROUND.into_iter().map(|round| round * decade).find(|range| *range * (1.0 - ROUNDING) > span)
 }
 
 /// Greatest common divisor of the differences of successive values; none if they have none but rounding.
