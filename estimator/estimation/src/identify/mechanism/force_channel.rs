@@ -31,8 +31,13 @@ pub fn take_defects_out(
     // Two fits also describe a step or a stretch, and leave as much as these.
     let is_change = |rms: f64| change.is_some_and(|change| change.rms[1].powi(2) < (1.0 - OF_POWER) * rms.powi(2));
     let steps = zero_step::zero_steps(pieces, &terms, known);
+    // A force that came and went is two steps, too.
+    let is_stretch = |rms: f64| {
+        let stretch = if steps.len() > 1 { foreign_force::stretch(pieces, &terms, known) } else { None };
+        stretch.is_some_and(|stretch| rms.powi(2) > (1.0 - OF_POWER) * stretch.outside.powi(2))
+    };
     let stepped = (!steps.is_empty()).then(|| zero_step::with_steps(&steps, pieces, &terms, known));
-    if let Some((stepped, _)) = stepped.filter(|(_, rms)| !is_change(*rms)) {
+    if let Some((stepped, _)) = stepped.filter(|(_, rms)| !is_change(*rms) && !is_stretch(*rms)) {
         if of.meta.repairs(TARE_STEP) {
             pieces.clone_from_slice(&stepped);
             terms.push(Term::ZeroStep);
