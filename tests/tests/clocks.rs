@@ -1,6 +1,7 @@
 //! Slides whose recorded rate contradicts their clock, and slides whose friction falls with the speed.
 
 use blind::Chance;
+use estimator::diagnose::{Options, Verdict, diagnose};
 use estimator::estimate::{Fit, Parameter};
 use estimator::identify::mechanism::fit;
 use estimator::log;
@@ -65,4 +66,20 @@ fn friction_that_falls_with_the_speed_is_no_negative_viscous_friction() {
         fallen += usize::from(found.warnings.iter().any(|w| w.contains("falls as the speed rises")));
     }
     assert!(fallen >= 6, "{fallen} of 8");
+}
+
+/// Stamps of arrival at 250 Hz, late by up to 3 ms, leave a white residual far above the noise of the force.
+#[test]
+fn a_jittering_clock_is_not_taken_for_noise() {
+    let mut chance = Chance::new(SEED, 3);
+    let verdict = |chance: &mut Chance, late_s: f64| {
+        let mut slide = slide(chance, &|speed| 0.8 + 3.0 * speed, 1.0);
+        slide.keep(&(0..5_000).map(|k| 2 * k).collect::<Vec<_>>());
+        slide.channels.retain(|channel| channel.name != "dq_m_s");
+        slide.time_s.iter_mut().flatten().for_each(|t| *t += chance.between(0.0, late_s));
+        slide.warnings = log::check(&slide);
+        diagnose(&[slide], &Options::default()).expect("an answer").verdict
+    };
+    assert_eq!(verdict(&mut chance, 0.0), Verdict::None);
+    assert_ne!(verdict(&mut chance, 0.003), Verdict::None);
 }

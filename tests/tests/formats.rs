@@ -6,8 +6,10 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
+use tests::drawer::{Sample, drawer, is_the_drawer};
 
 const ROWS: usize = 300;
+const MAPPED: &str = r#"{"task": "mechanism", "columns": {"t_s": "Time", "q_m": "Pos", "f_N": "Force"}}"#;
 
 fn recording() -> Recording {
     let channel = |name: &str, unit: &str, k: f64| Channel {
@@ -201,4 +203,37 @@ fn rerun_imports_our_mcap() {
     let Some(found) = python("read_rerun.py", &path) else { return };
     assert!(found["paths"].as_array().is_some_and(|p| p.iter().any(|p| p == "/recording")), "{found}");
     assert!(found["rows"].as_u64().is_some_and(|n| n >= ROWS as u64), "{found}");
+}
+
+/// Rows of the drawer below a head.
+fn below(head: &str, row: impl Fn(Sample) -> String) -> String {
+    std::iter::once(head.to_owned()).chain(drawer(1500, 100.0).into_iter().map(row)).collect::<Vec<_>>().join("\n")
+}
+
+/// Two signals of `TwinCAT` Scope, with the clocks of both in milliseconds.
+#[test]
+fn exports_of_twincat_scope_are_read() {
+    let head = "Name\tdrawer\nFile\tC:\\drawer.csv\nStarttime of export\t132959733843760000\tMontag, 2. Mai 2022\n\n\
+        Name\tPos\tName\tForce\nData-Type\tLREAL\tData-Type\tREAL32\nSampleTime[ms]\t10\tSampleTime[ms]\t10\n\
+        Unit\tmm (Length)\tUnit\tmN (Force)\n";
+    let row = |[t, place, push]: Sample| format!("{:.0}\t{:.4}\t{0:.0}\t{:.2}", 1e3 * t, 1e3 * place, 1e3 * push);
+    is_the_drawer(
+        "TwinCAT",
+        below(head, |sample| row(sample).replace('.', ",")),
+        &MAPPED.replace("\"Time\"", "\"time\""),
+    );
+}
+
+/// A unit in the next cell, and one in a line above the names; a conversion of counts there is told.
+#[test]
+fn units_beside_and_above_a_table_are_used() {
+    let beside = below("Time,Force,Force_unit,Pos,Pos_unit", |[t, place, push]| {
+        format!("{t:.2},{:.4},mN,{:.3},mm", 1e3 * push, 1e3 * place)
+    });
+    is_the_drawer("beside", beside, MAPPED);
+    let above = "Force units: mN\nCounts per Unit Torque: 16000\nPos unit,mm\nTime,Pos,Force";
+    let above = below(above, |[t, place, push]| format!("{t:.2},{:.3},{:.4}", 1e3 * place, 1e3 * push));
+    let read = is_the_drawer("above", above, MAPPED);
+    let said = |words: &str| read.warnings.iter().any(|warning| warning.text.contains(words));
+    assert!(said("the unit of `Force` is that of the line") && said("conversion of counts"), "{:?}", read.warnings);
 }

@@ -289,8 +289,7 @@ impl<'a, 'p> Reader<'a, 'p> {
             self.part.text_columns.push(column);
             return Ok(());
         }
-        let shown = String::from_utf8_lossy(cell).chars().take(40).collect::<String>();
-        let is_out = cell.is_empty() || self.layout.plan.is_missing(&shown);
+        let is_out = cell.is_empty() || self.layout.plan.is_missing(&String::from_utf8_lossy(cell));
         if is_out || !required {
             // The whole column decides whether that is a fault.
             let left_out =
@@ -301,6 +300,7 @@ impl<'a, 'p> Reader<'a, 'p> {
             self.row.push(MISSING);
             return Ok(());
         }
+        let shown = String::from_utf8_lossy(cell).chars().take(40).collect::<String>();
         let what = match value {
             Some(_) => format!("`{shown}` is not a finite number"),
             None if has_unit(cell) => format!("`{shown}` holds a unit, which belongs into the name of the column"),

@@ -212,6 +212,24 @@ fn units_in_the_metadata_are_those_of_the_columns() {
     }
 }
 
+#[test]
+fn rows_with_a_value_that_is_stated_to_be_missing_are_left_out() {
+    let read = |pushed: &[f64], meta: &str| {
+        let schema = "message m { required double t_s; required double q_m; required double f_N; }";
+        let mut out = Out::new(schema, Compression::SNAPPY);
+        let column = |values| put::<DoubleType>((values, None, None));
+        out.block(&[&column(&[0.0, 0.1, 0.2, 0.3]), &column(&[1.0, 2.0, 4.0, 3.0]), &column(pushed)]);
+        out.load(meta).map_err(|error| error.to_string())
+    };
+    let refused = read(&[5.0, f64::NAN, 6.0, 7.0], "{}").expect_err("no number");
+    assert!(refused.contains("\"missing\": [\"NaN\"] in the sidecar"), "{refused}");
+    let log = read(&[5.0, f64::NAN, 6.0, 7.0], r#"{"missing": ["NaN"]}"#).expect("loads");
+    assert_eq!(log.channel("q_m"), Some(&[1.0, 4.0, 3.0][..]));
+    assert!(said(&log, "1 row(s) without a value of `f_N` are left out"), "{:?}", log.warnings);
+    let refused = read(&[f64::NAN; 4], r#"{"missing": ["NaN"]}"#).expect_err("no value at all");
+    assert!(refused.contains("no row holds a value"), "{refused}");
+}
+
 /// pandas keeps an index without a name as `__index_level_0__`.
 #[test]
 fn the_index_of_a_data_frame_is_a_clock() {

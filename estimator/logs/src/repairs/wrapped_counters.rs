@@ -29,9 +29,8 @@ const ROUNDING: f64 = 1e-7;
 /// Lets the values of counters go on where they ran over.
 pub fn unwrap(recording: &mut Recording) -> Vec<Warning> {
     let mut found = Vec::new();
-    let gaps = gaps(recording);
     for k in 0..recording.channels.len() {
-        let Some((range, overruns)) = overruns(&recording.channels[k], &gaps) else { continue };
+        let Some((range, overruns)) = overruns(&recording.channels[k], recording.time_s.as_ref()) else { continue };
         let channel = &recording.channels[k];
         let text = format!(
             "{} runs over the end of its counter {} time(s), first at {}: its values go on from there",
@@ -60,17 +59,17 @@ fn go_on(channel: &mut Channel, range: f64, overruns: &[usize]) {
     }
 }
 
-/// True for the rows behind a gap of the clock, and for all rows without a clock: a position may be another one there.
-fn gaps(recording: &Recording) -> Vec<bool> {
-    let Some(time) = &recording.time_s else { return vec![true; recording.len()] };
-    let mut steps: Vec<f64> = time.windows(2).map(|w| w[1] - w[0]).collect();
+/// True if the clock runs on at all of these rows. Without a clock, and behind a gap, a position may be another one.
+fn runs_on(time_s: Option<&Vec<f64>>, rows: &[usize]) -> bool {
+    let Some(time_s) = time_s else { return false };
+    let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
     let middle = steps.len() / 2;
-    let usual = if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
-    std::iter::once(true).chain(time.windows(2).map(|w| w[1] - w[0] > 2.0 * usual)).collect()
+    let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    rows.iter().all(|row| time_s[*row] - time_s[row - 1] <= 2.0 * usual)
 }
 
 /// Range of a counter that ran over, and the samples at which it did. A scale of round length does so only where the clock runs on.
-fn overruns(channel: &Channel, gaps: &[bool]) -> Option<(f64, Vec<usize>)> {
+fn overruns(channel: &Channel, time_s: Option<&Vec<f64>>) -> Option<(f64, Vec<usize>)> {
     let values = channel.values.as_slice();
     let is_force = matches!(channel.unit.as_str(), "N" | "Nm");
     if values.len() < 3 || !(is_position(channel) || is_force && units::is_program_name(&channel.name)) {
@@ -88,8 +87,8 @@ fn overruns(channel: &Channel, gaps: &[bool]) -> Option<(f64, Vec<usize>)> {
     let least = if is_force { BITS_OF_FORCE } else { 0 };
     let of_bits = |unit: f64| BITS.iter().filter(|bits| **bits >= least).map(move |bits| unit * 2_f64.powi(*bits));
     let binary = unit.and_then(|unit| of_bits(unit).find(fits));
-    let runs_on = || !is_force && leaps.iter().all(|leap| !gaps[*leap]);
-    let range = binary.or_else(|| round_range(span).filter(|range| fits(range) && runs_on()))?;
+    let round = || round_range(span).filter(|range| !is_force && fits(range) && runs_on(time_s, &leaps));
+    let range = binary.or_else(round)?;
     let unit = unit.unwrap_or(0.0);
     // A force counts from an end of its range, or from the middle; the origin of a position may have been moved.
     let begins_at = |start: f64| low >= start - 0.5 * unit && high < start + range + 0.5 * unit;
